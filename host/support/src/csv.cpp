@@ -82,13 +82,23 @@ std::optional<std::size_t> CsvReader::find_column(std::string_view name) const {
   return static_cast<std::size_t>(found - columns_.begin());
 }
 
-std::optional<std::size_t> CsvReader::find_column(std::span<const std::string_view> names) const {
-  for (const std::string_view name : names) {
-    if (const std::optional<std::size_t> found = find_column(name)) {
-      return found;
+std::vector<std::size_t> CsvReader::find_columns(
+    std::span<const std::array<std::string_view, 3>> names, const std::string& remedy) const {
+  std::vector<std::size_t> found;
+  for (const std::array<std::string_view, 3>& possible : names) {
+    std::optional<std::size_t> column;
+    if (columns_.empty()) {
+      column = found.size();
     }
+    for (const std::string_view name : possible) {
+      column = column ? column : find_column(name);
+    }
+    if (!column) {
+      refuse(fmt::format("no column is named {}", possible.front()), remedy);
+    }
+    found.push_back(*column);
   }
-  return std::nullopt;
+  return found;
 }
 
 bool CsvReader::next_row() {

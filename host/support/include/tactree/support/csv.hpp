@@ -11,6 +11,7 @@
 // with '#' and a carriage return at the end of a line are ignored, and the end of a file of a
 // program that was cut off (GrowingFile): in FILE.incomplete, a last line without a line break.
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
@@ -59,9 +60,10 @@ class CsvReader {
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
   /// Index of the named column; nullopt if the header does not have it.
   [[nodiscard]] std::optional<std::size_t> find_column(std::string_view name) const;
-  /// Index of the first of these names that the header has.
-  [[nodiscard]] std::optional<std::size_t> find_column(
-      std::span<const std::string_view> names) const;
+  /// Indices of columns of which each has one of its `names`, the first that the header has; 0, 1,
+  /// 2 and so on without a header. `remedy`: what to do if the header lacks one.
+  [[nodiscard]] std::vector<std::size_t> find_columns(
+      std::span<const std::array<std::string_view, 3>> names, const std::string& remedy) const;
 
   /// Advances to the next row. Returns false at the end of the file. With a required header, a row
   /// must have as many cells as the header.

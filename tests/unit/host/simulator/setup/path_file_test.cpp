@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "folder_test.hpp"
 #include "message_of.hpp"
@@ -61,10 +62,13 @@ TEST_F(PathFile, ErrorsStatePlaceAndRemedy) {
   EXPECT_EQ(refusal("0,0,0,0\n1,,0,0\n"), ": line 2: column 2 is not a number: ''");
   EXPECT_EQ(refusal("t_s,x,y,z\nt_s,x,y,z\n0,0,0,0\n"),
             ": line 2: column 1 (t_s) is not a number: 't_s'");
-  for (const char* const names : {"t_ms,x,y,z", "t_s,x_mm,y_mm,z_mm", "a,b"}) {
+  for (const auto& [names, missing] : {std::pair{"t_ms,x,y,z", "t_s"},
+                                       {"t_s,x_mm,y_mm,z_mm", "x"},
+                                       {"t_s,x,z", "y"},
+                                       {"a,b", "t_s"}}) {
     EXPECT_EQ(refusal(std::string(names) + "\n0,0,0,0\n"),
-              ": line 1: the names of the columns do not include t_s, x, y and z (name them, in "
-              "seconds and metres, or omit the line of names)");
+              std::string(": line 1: no column is named ") + missing +
+                  " (name them, in seconds and metres, or omit the line of names)");
   }
   EXPECT_EQ(refusal("0,0,0,0\n0,0,0,0\n"),
             ": line 2: the time does not ascend (sort the rows by t_s)");
