@@ -16,7 +16,6 @@
 #include "mesh_import/slicer_volumes.hpp"
 #include "mesh_import/xml_document.hpp"
 #include "mesh_import/zip_archive.hpp"
-#include "src/readers/number.hpp"
 
 namespace tactree::builder {
 namespace {

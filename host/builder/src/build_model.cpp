@@ -295,7 +295,7 @@ class Pipeline {
     return blob;
   }
 
-  /// The spacing was chosen before the model was turned by a pose, and its sheet thickened.
+  /// The spacing was chosen before the sheet was thickened.
   void check_budget(std::uint64_t bytes, std::uint64_t budget) {
     if (bytes > budget) {
       throw std::runtime_error(

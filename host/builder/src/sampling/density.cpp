@@ -221,6 +221,11 @@ class DensityChooser {
   [[nodiscard]] std::uint64_t bytes_of(const DensityChoice& choice) const {
     Model model;
     model.positions = choice.points.positions();
+    if (options_.pose) {  // the octree lies along the axes of the device
+      for (Eigen::Vector3d& position : model.positions) {
+        position = *options_.pose * position;
+      }
+    }
     model.normals.assign(model.positions.size(), Eigen::Vector3f::UnitZ());
     model.spacing_m = choice.spacing_m;
     model.support_radius_m = kSupportSpacings * choice.spacing_m;
