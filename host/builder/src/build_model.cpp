@@ -78,12 +78,13 @@ class Pipeline {
     model_.largest_gap_m = gaps.largest_m;
     report_.openings = std::move(gaps.openings);
     model_.source_digest = digest();
-    model_.positions = choice.points.positions();
-    model_.normals = choice.points.normals();
+    Cloud points = choice.points.take();
+    model_.positions = std::move(points.positions);
+    model_.normals = std::move(points.normals);
     if (options_.pose) {
       place(*options_.pose);
     }
-    WrittenBlob blob = write(choice);
+    WrittenBlob blob = write(points);
     hint_at_axis();
     return blob;
   }
@@ -103,7 +104,7 @@ class Pipeline {
   }
 
   // Only if the shape indicates an axis and the user has not stated which axis points up. In the
-  // axes of the file, to which --axis refers.
+  // axes of the file, to which --axis refers. The last use of the model, which is turned back.
   void hint_at_axis() {
     if (options_.up) {
       return;
@@ -112,18 +113,17 @@ class Pipeline {
     if (options_.pose) {
       back = back * options_.pose->linear().transpose();
     }
-    const bool is_turned = options_.turn_deg != 0.0 || options_.pose;
-    std::vector<Eigen::Vector3d> positions = model_.positions;
-    std::vector<Eigen::Vector3f> normals = model_.normals;
     std::vector<Opening> openings = report_.openings;
-    for (std::size_t i = 0; i < positions.size() && is_turned; ++i) {
-      positions[i] = back * positions[i];
-      normals[i] = back.cast<float>() * normals[i];
+    if (options_.turn_deg != 0.0 || options_.pose) {
+      for (std::size_t i = 0; i < model_.positions.size(); ++i) {
+        model_.positions[i] = back * model_.positions[i];
+        model_.normals[i] = back.cast<float>() * model_.normals[i];
+      }
+      for (Opening& opening : openings) {
+        opening.centre = back * opening.centre;
+      }
     }
-    for (std::size_t i = 0; i < openings.size() && is_turned; ++i) {
-      openings[i].centre = back * openings[i].centre;
-    }
-    const auto posture = lying_posture(positions, normals, openings, model_.spacing_m,
+    const auto posture = lying_posture(model_.positions, model_.normals, openings, model_.spacing_m,
                                        report_.backed_share < kBodyShare);
     if (posture) {
       report_.notes.push_back(fmt::format("{} ({}; --axis z keeps it as it is)",
@@ -272,11 +272,14 @@ class Pipeline {
     return choice.dense_spacing_m > 0.0 ? choice.dense_spacing_m : choice.spacing_m;
   }
 
-  WrittenBlob write(const DensityChoice& choice) {
-    begin_stage("writing the octree", choice);
-    model_.material_indices = choice.points.cloud().materials;
+  /// `points`: the materials, colours and doubts of the points of the model.
+  WrittenBlob write(const Cloud& points) {
+    stages_.begin("writing the octree");
+    stages_.set_points(model_.positions.size());
+    model_.material_indices = points.materials;
     model_.tells_interior = true;
-    model_.doubtful = doubts_of(choice);
+    const bool as_given = doubtful_.empty() && !options_.two_sided_m;
+    model_.doubtful = as_given ? points.doubtful : doubtful_;
     WrittenBlob blob = write_blob(model_);
     check(blob);
     if (options_.flash_budget_bytes) {
@@ -284,7 +287,7 @@ class Pipeline {
     }
     count_materials(blob);
     collect_doubtful(blob);
-    collect_colours(blob, choice.points.cloud());
+    collect_colours(blob, points);
     report_.spacing_m = model_.spacing_m;
     report_.largest_gap_m = model_.largest_gap_m;
     report_.merged = blob.merged;
@@ -308,10 +311,6 @@ class Pipeline {
         "the flash budget of {} bytes allows a spacing of {}: {} bytes, {:.1f} % of the budget{}",
         budget, length_text(model_.spacing_m), bytes, part,
         part < 90.0 && !mesh_ ? "; the scan has no finer detail" : ""));
-  }
-
-  std::vector<std::uint8_t> doubts_of(const DensityChoice& choice) const {
-    return doubtful_.empty() && !options_.two_sided_m ? choice.points.cloud().doubtful : doubtful_;
   }
 
   void collect_doubtful(const WrittenBlob& blob) {

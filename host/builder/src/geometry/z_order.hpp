@@ -35,7 +35,7 @@ struct Neighbour {
 void keep_nearest(std::size_t count, std::vector<Neighbour>& found);
 
 /// A cloud in Z order. Preconditions: finite positions, at most 2^32 - 2 of them. Only keep(),
-/// transform() and set_normals() modify it.
+/// transform(), set_normals() and take() modify it.
 class ZOrderedCloud {
  public:
   static constexpr int kFinestLevel = kMortonLevels;
@@ -57,6 +57,12 @@ class ZOrderedCloud {
   /// Replaces each position by factor * (position - origin).
   void transform(const Eigen::Vector3d& origin, double factor);
   void set_normals(std::vector<Eigen::Vector3f> normals) { cloud_.normals = std::move(normals); }
+  /// Returns the points; none are left.
+  [[nodiscard]] Cloud take() {
+    ZOrderedCloud all;
+    std::swap(all, *this);
+    return std::move(all.cloud_);
+  }
 
   /// Edge of the cells of a level; level 0 is one cell around all points.
   [[nodiscard]] double cell_edge(int level) const;

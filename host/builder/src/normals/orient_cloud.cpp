@@ -1,6 +1,6 @@
 #include "normals/orient_cloud.hpp"
 
-#include <tbb/parallel_sort.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,34 +28,27 @@ constexpr double kFewEvidence = 0.03;  // ratio of the points below which a comp
 constexpr double kFlatSheet = 0.5;     // minimum mean normal of a sheet that faces one way
 constexpr std::size_t kParitySamples = 9;
 
-// Neighbours in compressed row storage.
-struct Adjacency {
-  struct Link {
-    std::uint32_t to;
-    float weight;
-  };
-  std::vector<std::uint32_t> first;
-  std::vector<Link> links;
-  [[nodiscard]] std::span<const Link> of(std::uint32_t i) const {
-    return std::span(links).subspan(first[i], first[i + 1] - first[i]);
-  }
+struct PatchLink {
+  std::uint32_t from;
+  SignedLink link;
 };
 
-Adjacency adjacency_of(std::size_t nodes, const std::vector<SignedEdge>& edges) {
-  Adjacency a;
-  a.first.assign(nodes + 1, 0);
-  for (const SignedEdge& e : edges) {
-    ++a.first[e.from + 1];
-    ++a.first[e.to + 1];
+// Each link in the rows of both of its ends.
+SignedGraph graph_of(std::size_t nodes, const std::vector<PatchLink>& both_ways) {
+  SignedGraph graph;
+  graph.first.assign(nodes + 1, 0);
+  for (const PatchLink& l : both_ways) {
+    ++graph.first[l.from + 1];
+    ++graph.first[l.link.to + 1];
   }
-  std::partial_sum(a.first.begin(), a.first.end(), a.first.begin());
-  a.links.resize(a.first[nodes]);
-  std::vector<std::uint32_t> next(a.first.begin(), a.first.end() - 1);
-  for (const SignedEdge& e : edges) {
-    a.links[next[e.from]++] = {e.to, e.weight};
-    a.links[next[e.to]++] = {e.from, e.weight};
+  std::partial_sum(graph.first.begin(), graph.first.end(), graph.first.begin());
+  graph.links.resize(graph.first[nodes]);
+  std::vector<std::uint32_t> next(graph.first.begin(), graph.first.end() - 1);
+  for (const PatchLink& l : both_ways) {
+    graph.links[next[l.from]++] = l.link;
+    graph.links[next[l.link.to]++] = {l.from, l.link.weight};
   }
-  return a;
+  return graph;
 }
 
 struct Belief {
@@ -68,7 +61,7 @@ struct Belief {
 
 // Determines the signs of the nodes. The node with the strongest belief is decided first and passes
 // its sign on to its neighbours.
-std::vector<std::int8_t> decide(std::vector<float> belief, const Adjacency& links) {
+std::vector<std::int8_t> decide(std::vector<float> belief, const SignedGraph& graph) {
   const auto nodes = static_cast<std::uint32_t>(belief.size());
   std::vector<std::int8_t> sign(nodes, 0);
   std::priority_queue<Belief> queue;
@@ -92,7 +85,7 @@ std::vector<std::int8_t> decide(std::vector<float> belief, const Adjacency& link
       continue;
     }
     sign[top.node] = belief[top.node] < 0.0F ? -1 : 1;
-    for (const Adjacency::Link& link : links.of(top.node)) {
+    for (const SignedLink& link : graph.of(top.node)) {
       if (sign[link.to] == 0) {
         belief[link.to] += static_cast<float>(sign[top.node]) * link.weight;
         queue.push({std::abs(belief[link.to]), link.to});
@@ -108,11 +101,13 @@ class Orienter {
       : in_(input), normals_(normals) {}
 
   CloudOrientation run() {
-    const std::vector<SignedEdge> edges = signed_graph(in_.points, normals_, in_.spacing);
-    number_pieces(edges);
-    collect_evidence();
-    sign_ = decide_points(edges);
-    smooth(edges);
+    {
+      const SignedGraph graph = signed_graph(in_.points, normals_, in_.spacing);
+      number_pieces(graph);
+      collect_evidence();
+      sign_ = decide_points(graph);
+      smooth(graph);
+    }
     judge_pieces();
     for (std::size_t i = 0; i < sign_.size(); ++i) {
       if (sign_[i] < 0) {
@@ -135,11 +130,13 @@ class Orienter {
   }
 
   // Numbers the connected components of the graph, ascending by lowest point.
-  void number_pieces(const std::vector<SignedEdge>& edges) {
+  void number_pieces(const SignedGraph& graph) {
     DisjointSets sets(size());
-    for (const SignedEdge& e : edges) {
-      sets.join(e.from, e.to);
-    }
+    tbb::parallel_for(0U, graph.size(), [&](std::uint32_t i) {
+      for (const SignedLink& link : graph.of(i)) {
+        sets.join(i, link.to);
+      }
+    });
     piece_.resize(size());
     for (std::uint32_t i = 0; i < size(); ++i) {
       const std::uint32_t r = sets.find(i);
@@ -225,15 +222,17 @@ class Orienter {
   }
 
   // Joins points of certain relative sign to patches, then determines the signs of the patches.
-  std::vector<std::int8_t> decide_points(const std::vector<SignedEdge>& edges) {
-    const Patches patches = certain_patches(edges, evidence_.side, kCertain);
-    std::vector<SignedEdge> between;
-    for (const SignedEdge& e : edges) {
-      const std::uint32_t a = patches.of_point[e.from];
-      const std::uint32_t b = patches.of_point[e.to];
-      if (a != b) {
-        const bool opposite = patches.reversed[e.from] != patches.reversed[e.to];
-        between.push_back({std::min(a, b), std::max(a, b), opposite ? -e.weight : e.weight});
+  std::vector<std::int8_t> decide_points(const SignedGraph& graph) {
+    const Patches patches = certain_patches(graph, evidence_.side, kCertain);
+    std::vector<PatchLink> between;
+    for (std::uint32_t i = 0; i < size(); ++i) {
+      for (const SignedLink& link : graph.of(i)) {
+        const std::uint32_t a = patches.of_point[i];
+        const std::uint32_t b = patches.of_point[link.to];
+        if (a != b) {
+          const bool opposite = patches.reversed[i] != patches.reversed[link.to];
+          between.push_back({a, {b, opposite ? -link.weight : link.weight}});
+        }
       }
     }
     std::vector<float> belief(patches.count, 0.0F);
@@ -242,7 +241,7 @@ class Orienter {
       belief[patches.of_point[i]] += patches.reversed[i] != 0 ? -own : own;
     }
     const std::vector<std::int8_t> of_patch =
-        decide(std::move(belief), adjacency_of(patches.count, between));
+        decide(std::move(belief), graph_of(patches.count, between));
     std::vector<std::int8_t> sign(size());
     for (std::size_t i = 0; i < size(); ++i) {
       const std::int8_t s = of_patch[patches.of_point[i]];
@@ -252,17 +251,19 @@ class Orienter {
   }
 
   // Gives points the sign of most of their neighbours, unless their own evidence is stronger.
-  void smooth(const std::vector<SignedEdge>& edges) {
-    const Adjacency links = adjacency_of(size(), edges);
+  void smooth(const SignedGraph& graph) {
+    const SignedGraph others = transposed(graph);
     contested_.assign(size(), 0);
     for (int sweep = 0; sweep < kSmoothingSweeps; ++sweep) {
       bool changed = false;
       for (std::uint32_t i = 0; i < size(); ++i) {
         float field = evidence_.side[i] + hint_[i];
         float most = std::abs(field);
-        for (const Adjacency::Link& link : links.of(i)) {
-          field += link.weight * static_cast<float>(sign_[link.to]);
-          most += std::abs(link.weight);
+        for (const std::span<const SignedLink> row : {graph.of(i), others.of(i)}) {
+          for (const SignedLink& link : row) {
+            field += link.weight * static_cast<float>(sign_[link.to]);
+            most += std::abs(link.weight);
+          }
         }
         const float support = field * static_cast<float>(sign_[i]);
         if (support < 0.0F) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "geometry/local_points.hpp"
 
@@ -58,11 +59,10 @@ std::vector<Nearest> nearest_neighbours(const ZOrderedCloud& points, double spac
   return nearest;
 }
 
-void add_edges_of(std::uint32_t i, const ZOrderedCloud& points,
+void add_links_of(std::uint32_t i, const ZOrderedCloud& points,
                   std::span<const Eigen::Vector3f> normals, const std::vector<Nearest>& nearest,
-                  std::vector<SignedEdge>& edges) {
+                  std::vector<SignedLink>& links) {
   for (const std::uint32_t j : nearest[i]) {
-    // If both ends list the edge, the lower one adds it.
     const bool listed_by_lower =
         j < i && std::find(nearest[j].begin(), nearest[j].end(), i) != nearest[j].end();
     if (j == i || listed_by_lower) {
@@ -70,7 +70,7 @@ void add_edges_of(std::uint32_t i, const ZOrderedCloud& points,
     }
     const float weight = weight_of(points, normals, i, j);
     if (weight != 0.0F) {
-      edges.push_back({std::min(i, j), std::max(i, j), weight});
+      links.push_back({j, weight});
     }
   }
 }
@@ -111,13 +111,13 @@ class SignedSets {
     return place;
   }
   // The lowest member becomes the root.
-  void join(const SignedEdge& edge) {
-    const Place a = find(edge.from);
-    const Place b = find(edge.to);
+  void join(std::uint32_t from, SignedLink link) {
+    const Place a = find(from);
+    const Place b = find(link.to);
     if (a.root == b.root) {
       return;
     }
-    const bool reverse = (a.reversed ^ b.reversed ^ (edge.weight < 0.0F ? 1 : 0)) != 0;
+    const bool reverse = (a.reversed ^ b.reversed ^ (link.weight < 0.0F ? 1 : 0)) != 0;
     const float of_a = evidence_[a.root];
     const float of_b = reverse ? -evidence_[b.root] : evidence_[b.root];
     if (of_a * of_b < 0.0F && std::min(std::abs(of_a), std::abs(of_b)) > kContradiction) {
@@ -138,50 +138,81 @@ class SignedSets {
 
 }  // namespace
 
-std::vector<SignedEdge> signed_graph(const ZOrderedCloud& points,
-                                     std::span<const Eigen::Vector3f> normals, double spacing) {
-  const std::vector<Nearest> nearest = nearest_neighbours(points, spacing);
+SignedGraph signed_graph(const ZOrderedCloud& points, std::span<const Eigen::Vector3f> normals,
+                         double spacing) {
+  std::vector<Nearest> nearest = nearest_neighbours(points, spacing);
   // Each part of the points has a list of its own, so that their order does not depend on threads.
   constexpr std::size_t kPart = 8192;
-  std::vector<std::vector<SignedEdge>> parts((points.size() + kPart - 1) / kPart);
+  std::vector<std::vector<SignedLink>> parts((points.size() + kPart - 1) / kPart);
+  SignedGraph graph;
+  graph.first.resize(points.size() + 1);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     const auto end = static_cast<std::uint32_t>(std::min(points.size(), (part + 1) * kPart));
     parts[part].reserve(6 * kPart);
     for (auto i = static_cast<std::uint32_t>(part * kPart); i < end; ++i) {
-      add_edges_of(i, points, normals, nearest, parts[part]);
+      const std::size_t before = parts[part].size();
+      add_links_of(i, points, normals, nearest, parts[part]);
+      graph.first[i + 1] = static_cast<std::uint32_t>(parts[part].size() - before);
     }
   });
-  std::size_t count = 0;
-  for (const std::vector<SignedEdge>& part : parts) {
-    count += part.size();
-  }
-  std::vector<SignedEdge> edges;
-  edges.reserve(count);
-  for (std::vector<SignedEdge>& part : parts) {
-    edges.insert(edges.end(), part.begin(), part.end());
+  nearest = {};
+  std::partial_sum(graph.first.begin(), graph.first.end(), graph.first.begin());
+  graph.links.reserve(graph.first.back());
+  for (std::vector<SignedLink>& part : parts) {
+    graph.links.insert(graph.links.end(), part.begin(), part.end());
     part = {};
   }
-  return edges;
+  return graph;
 }
 
-Patches certain_patches(const std::vector<SignedEdge>& edges, std::span<const float> evidence,
-                        float least_weight) {
-  const std::size_t points = evidence.size();
-  // Sorts by certainty in steps, which makes it a counting sort.
-  constexpr int kCertaintySteps = 64;
-  std::array<std::vector<std::uint32_t>, kCertaintySteps + 1> by_certainty;
-  for (std::uint32_t e = 0; e < edges.size(); ++e) {
-    const float certainty = std::abs(edges[e].weight);
-    if (certainty >= least_weight) {
-      by_certainty[static_cast<std::size_t>(kCertaintySteps * std::min(certainty, 1.0F))].push_back(
-          e);
+SignedGraph transposed(const SignedGraph& graph) {
+  SignedGraph result;
+  result.first.resize(graph.first.size());
+  for (const SignedLink& link : graph.links) {
+    ++result.first[link.to + 1];
+  }
+  std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
+  result.links.resize(graph.links.size());
+  std::vector<std::uint32_t> next(result.first.begin(), result.first.end() - 1);
+  for (std::uint32_t i = 0; i < graph.size(); ++i) {
+    for (const SignedLink& link : graph.of(i)) {
+      result.links[next[link.to]++] = {i, link.weight};
     }
   }
-  SignedSets sets(evidence);
-  for (auto step = by_certainty.rbegin(); step != by_certainty.rend(); ++step) {
-    for (const std::uint32_t e : *step) {
-      sets.join(edges[e]);
+  return result;
+}
+
+Patches certain_patches(const SignedGraph& graph, std::span<const float> evidence,
+                        float least_weight) {
+  const std::size_t points = evidence.size();
+  // Sorts by certainty in steps, the most certain first: a counting sort.
+  constexpr std::size_t kCertaintySteps = 64;
+  const auto step_of = [&](SignedLink link) -> std::size_t {
+    const float certainty = std::min(std::abs(link.weight), 1.0F);
+    return kCertaintySteps - static_cast<std::size_t>(kCertaintySteps * certainty);
+  };
+  struct Certain {
+    std::uint32_t from;
+    std::uint32_t link;
+  };
+  std::array<std::size_t, kCertaintySteps + 2> first_of_step{};
+  const auto for_each_certain = [&](auto&& visit) {
+    for (std::uint32_t i = 0; i < graph.size(); ++i) {
+      for (std::uint32_t k = graph.first[i]; k < graph.first[i + 1]; ++k) {
+        if (std::abs(graph.links[k].weight) >= least_weight) {
+          visit(Certain{i, k});
+        }
+      }
     }
+  };
+  for_each_certain([&](Certain c) { ++first_of_step[step_of(graph.links[c.link]) + 1]; });
+  std::partial_sum(first_of_step.begin(), first_of_step.end(), first_of_step.begin());
+  std::vector<Certain> by_certainty(first_of_step.back());
+  for_each_certain(
+      [&](Certain c) { by_certainty[first_of_step[step_of(graph.links[c.link])]++] = c; });
+  SignedSets sets(evidence);
+  for (const Certain& c : by_certainty) {
+    sets.join(c.from, graph.links[c.link]);
   }
   Patches patches;
   patches.of_point.resize(points);
