@@ -128,7 +128,7 @@ std::string holes_markdown(const Result& result) {
         "\n## Openings of {}\nOpenings wider than the {:.3g} mm that the surface fit bridges: {}. "
         "Red: a hole, enclosed by surface; orange: an open boundary.\n\n"
         "![Openings of {}]({})\n",
-        scan.name, 1e3 * scan.support_m, scan.openings.size(), scan.name, map_name(i));
+        scan.name, 1e3 * scan.bridged_m, scan.openings.size(), scan.name, map_name(i));
     if (!scan.openings.empty()) {
       page += "\n| opening | width, mm | centre x, y, z, mm |\n|---|---|---|\n";
     }

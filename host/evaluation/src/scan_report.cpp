@@ -32,7 +32,7 @@ std::string openings_text(const ScanResult& scan) {
                                                builder::place_text(scan.openings[0].centre));
   return fmt::format(
       "holes: {}, open boundaries: {}, wider than the {} that the surface fit bridges{}", holes,
-      static_cast<std::ptrdiff_t>(scan.openings.size()) - holes, length_text(scan.support_m, 3),
+      static_cast<std::ptrdiff_t>(scan.openings.size()) - holes, length_text(scan.bridged_m, 3),
       widest);
 }
 

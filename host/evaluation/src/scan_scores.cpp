@@ -102,7 +102,7 @@ ScanResult score_scan(const std::filesystem::path& file, const Options& options)
     result.warnings = report.warnings;
     result.points = view.point_count();
     result.spacing_m = built.report.spacing_m;
-    result.support_m = static_cast<double>(view.header().support_radius_m);
+    result.bridged_m = builder::kBridgedSpacings * static_cast<double>(view.header().spacing_m);
     result.openings = built.report.openings;
     result.hole_map = hole_map_svg(view, result.openings);
     for (builder::Opening& opening : result.openings) {

@@ -41,6 +41,8 @@ constexpr double kAcrossCosine = 0.707;
 // Fraction of border points that must see the other side of their opening to classify it as a hole.
 constexpr double kHolePart = 0.5;
 constexpr std::size_t kLooks = 64;
+constexpr double kBridgedRadii = kBridgedSpacings / kSupportSpacings;
+constexpr double kBallStepRadii = 0.25;  // between the centres of the balls that a point sees
 // Minimum number of border points per spacing of diameter; fewer are noise.
 constexpr double kLeastPointsPerSpacing = 1.0;
 constexpr std::size_t kLeastPoints = 6;  // of a hole wider than the radius, and of any edge
@@ -232,6 +234,38 @@ bool is_hole(const ZOrderedCloud& border, const std::vector<std::uint32_t>& memb
   return static_cast<double>(met) > kHolePart * static_cast<double>(looks);
 }
 
+/// Border points, and the surface that they belong to.
+struct Border {
+  ZOrderedCloud points;               // the normals are the directions away from the surface
+  std::vector<std::uint32_t> of_all;  // number of each in `all`
+  const ZOrderedCloud& all;
+};
+
+// Diameter of the widest ball without points of this side of the body, up to `most`, whose centre
+// lies before a border point.
+double widest_ball(const Border& border, const std::vector<std::uint32_t>& members, double radius,
+                   double most) {
+  double widest = 0.0;
+  const std::size_t stride = 1 + (members.size() - 1) / kLooks;
+  for (std::size_t k = 0; k < members.size(); k += stride) {
+    const std::uint32_t i = members[k];
+    const Eigen::Vector3f& normal = border.all.normals()[border.of_all[i]];
+    for (double ahead = kBallStepRadii * radius; ahead < 0.5 * most + kBallStepRadii * radius;
+         ahead += kBallStepRadii * radius) {
+      const Eigen::Vector3d centre =
+          border.points.positions()[i] + ahead * border.points.normals()[i].cast<double>();
+      double squared = ahead * ahead;
+      border.all.visit_within(centre, ahead, [&](std::uint32_t j, double its) {
+        if (its < squared && normal.dot(border.all.normals()[j]) > kOtherSideCosine) {
+          squared = its;
+        }
+      });
+      widest = std::max(widest, 2.0 * std::sqrt(squared));
+    }
+  }
+  return std::min(widest, most);
+}
+
 Opening measure(const ZOrderedCloud& border, const std::vector<std::uint32_t>& members,
                 double spacing) {
   Opening opening;
@@ -294,18 +328,23 @@ Gaps find_gaps(const ZOrderedCloud& points, double spacing, double radius, bool 
   if (watertight) {
     return gaps;
   }
-  ZOrderedCloud border = points.subset(at_border);
-  border.set_normals(std::move(directions));
-  for (const auto& [root, members] : group(border, radius)) {
-    const Opening opening = measure(border, members, spacing);
+  Border border{points.subset(at_border), std::move(at_border), points};
+  border.points.set_normals(std::move(directions));
+  const double bridged = kBridgedRadii * radius;
+  for (const auto& [root, members] : group(border.points, radius)) {
+    Opening opening = measure(border.points, members, spacing);
     if (members.size() < kLeastPoints || static_cast<double>(members.size()) * spacing <
                                              kLeastPointsPerSpacing * opening.diameter_m) {
       continue;
     }
-    if (opening.kind == Opening::Kind::kHole) {
-      gaps.largest_m = std::max(gaps.largest_m, opening.diameter_m);
+    const bool hole = opening.kind == Opening::Kind::kHole;
+    const double most = hole ? opening.diameter_m : std::min(opening.diameter_m, 2.0 * radius);
+    const double ball = widest_ball(border, members, radius, most);
+    if (hole) {
+      opening.diameter_m = ball;
+      gaps.largest_m = std::max(gaps.largest_m, ball);
     }
-    if (opening.diameter_m > radius) {
+    if (ball > bridged) {
       gaps.openings.push_back(opening);
     }
   }

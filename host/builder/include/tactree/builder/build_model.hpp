@@ -32,6 +32,9 @@ namespace tactree::builder {
 /// candidates.
 inline constexpr double kSupportSpacings = 2.5;
 inline constexpr double kReachSpacings = 3.0;
+/// Maximum width of a hole, in spacings, over which a hand keeps contact with the full force. In
+/// wider ones the force fades, and from two support radii on a hand falls through.
+inline constexpr double kBridgedSpacings = 3.75;
 
 enum class UpAxis : std::uint8_t { kX, kY, kZ };
 
@@ -92,7 +95,7 @@ struct Opening {
     kBoundary,  ///< an open end or edge of the object
   };
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  double diameter_m = 0.0;
+  double diameter_m = 0.0;   ///< of a hole: its width; of a boundary: its largest extent
   std::uint32_t points = 0;  ///< at its border
   Kind kind = Kind::kHole;
 };
@@ -127,7 +130,7 @@ struct BuildReport {
   double spacing_m = 0.0;
   double largest_gap_m = 0.0;
   double backed_share = 0.0;      ///< ratio of points with material behind; others are on sheets
-  std::vector<Opening> openings;  ///< wider than the support radius, widest first
+  std::vector<Opening> openings;  ///< wider than kBridgedSpacings, widest first
   std::uint32_t pieces = 0;       ///< connected components if normals were estimated, else 0
   OrientationReport orientation;
 

@@ -8,7 +8,7 @@
 
 namespace tactree::builder {
 
-/// The openings wider than the support radius, widest first, as in the report of the build.
+/// The openings wider than kBridgedSpacings, widest first, as in the report of the build.
 /// Cost: about 5 us per point and core.
 [[nodiscard]] std::vector<Opening> find_openings(const core::BlobView& view);
 

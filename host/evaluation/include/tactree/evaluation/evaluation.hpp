@@ -135,8 +135,8 @@ struct ScanResult {
   std::vector<std::string> notes;     ///< of the build
   std::vector<std::string> warnings;  ///< of the build
   double spacing_m = 0.0;
-  double support_m = 0.0;                  ///< maximum radius that the surface fit bridges
-  std::vector<builder::Opening> openings;  ///< wider than support_m, in descending order of width;
+  double bridged_m = 0.0;                  ///< maximum width that the surface fit bridges
+  std::vector<builder::Opening> openings;  ///< wider than bridged_m, in descending order of width;
                                            ///< in the frame of the file, m
   std::string hole_map;                    ///< SVG picture of the openings
   Scores scores;
