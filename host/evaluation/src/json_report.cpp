@@ -122,6 +122,7 @@ Json slides(const SlideScores& s) {
           {"force_step_99_N", s.force_step_99_N},
           {"force_step_999_N", s.force_step_999_N},
           {"crossings", s.crossings},
+          {"crossings_late", s.late},
           {"crossings_missed", s.missed}};
 }
 

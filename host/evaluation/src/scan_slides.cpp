@@ -23,6 +23,7 @@ constexpr int kTicks = 300;                // per slide
 constexpr int kTriesPerSlide = 20;         // for a start at which the surface fit is valid
 constexpr double kCrossings_m_s[] = {0.1, 0.5, 1.0};
 constexpr double kNoticed_m = 1e-3;     // maximum depth at which a crossing is noticed
+constexpr int kLateTicks = 2;           // beyond, in which it is noticed late
 constexpr double kSpacingsAhead = 2.0;  // of a crossing's start before the surface
 
 struct ScanSpot {
@@ -85,21 +86,25 @@ class Slide {
   std::vector<double> steps_;  // change of the force in each tick, N
 };
 
-/// Moves straight through the surface by `step_m` per tick. Empty if the hand starts inside.
-std::optional<bool> notices_crossing(const core::BlobView& view, const ScanSpot& spot,
-                                     double step_m, double phase) {
+enum class Crossing { kFromInside, kNoticed, kLate, kMissed };
+
+/// Moves straight through the surface by `step_m` per tick.
+Crossing cross(const core::BlobView& view, const ScanSpot& spot, double step_m, double phase) {
   const double ahead = kSpacingsAhead * static_cast<double>(view.header().spacing_m);
   const auto at = [&](double depth) { return (spot.point - depth * spot.normal).eval(); };
   Touch touch(view, core::RenderMode::kSurface, at(-ahead));
   touch.to(at(-ahead));
   if (touch.to(at(-ahead)).inside) {  // known from the second tick on
-    return std::nullopt;
+    return Crossing::kFromInside;
   }
-  bool noticed = false;
-  for (double depth = phase * step_m - ahead; depth <= kNoticed_m && !noticed; depth += step_m) {
-    noticed = touch.to(at(depth)).in_contact;
+  int late = 0;
+  for (double depth = phase * step_m - ahead; late < kLateTicks; depth += step_m) {
+    late += depth > kNoticed_m ? 1 : 0;
+    if (touch.to(at(depth)).in_contact) {
+      return late == 0 ? Crossing::kNoticed : Crossing::kLate;
+    }
   }
-  return noticed;
+  return Crossing::kMissed;
 }
 
 }  // namespace
@@ -135,9 +140,10 @@ SlideScores slide_over(const core::BlobView& view, std::span<const Vector3d> poi
       steps.insert(steps.end(), slide.steps().begin(), slide.steps().end());
     }
     for (const double speed : kCrossings_m_s) {
-      const auto noticed = notices_crossing(view, *begin, speed * kPeriodS, unit(random));
-      scores.crossings += noticed ? 1 : 0;
-      scores.missed += noticed && !*noticed ? 1 : 0;
+      const Crossing crossing = cross(view, *begin, speed * kPeriodS, unit(random));
+      scores.crossings += crossing != Crossing::kFromInside ? 1 : 0;
+      scores.late += crossing == Crossing::kLate ? 1 : 0;
+      scores.missed += crossing == Crossing::kMissed ? 1 : 0;
     }
   }
   scores.force_error_rms_N =

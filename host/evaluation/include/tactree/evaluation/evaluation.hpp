@@ -117,7 +117,8 @@ struct SlideScores {
   double force_step_99_N = 0.0;
   double force_step_999_N = 0.0;
   int crossings = 0;  ///< straight through the surface, at 0.1, 0.5 and 1 m/s
-  int missed = 0;     ///< of these: no contact within 1 mm behind the surface
+  int late = 0;       ///< of these: contact not within 1 mm behind the surface, but two ticks later
+  int missed = 0;     ///< of these: no contact
 };
 
 struct ScanResult {
