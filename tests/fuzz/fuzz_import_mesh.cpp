@@ -23,6 +23,7 @@
 namespace {
 
 using namespace tactree::builder;
+using tactree::fuzz::Folder;
 using tactree::fuzz::require;
 
 void examine(const ImportedMesh& mesh) {
@@ -40,23 +41,6 @@ void examine(const ImportedMesh& mesh) {
 void examine(const SceneNotes& notes) {
   require(!std::isnan(notes.unit_m) && notes.unit_m >= 0.0, "a unit that is no length");
 }
-
-/// A folder of this process, outside of which a scene may name no file.
-class Folder {
- public:
-  Folder() {
-    std::string name = std::filesystem::temp_directory_path() / "fuzz-import-XXXXXX";
-    require(::mkdtemp(name.data()) != nullptr, "no folder can be made");
-    path_ = name;
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// Reads by one reader.
 template <typename Read>

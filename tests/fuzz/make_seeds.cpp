@@ -5,10 +5,12 @@
 //   import_mesh/<what>          a triangle in every format of the import process
 //   read_device, read_firmware, read_materials, read_rows, read_scene
 //                               accepted files, and texts of options
+//   read_trace/<format>         a recording of two ticks
 
 #include <elf.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -30,6 +32,7 @@
 #include "tactree/runtime/image_record.hpp"
 #include "tactree/simulation/injection.hpp"
 #include "tactree/support/device_file.hpp"
+#include "tactree/telemetry/tick_file.hpp"
 #include "wire_seeds.hpp"
 
 namespace {
@@ -404,6 +407,20 @@ void write_materials(const fs::path& folder) {
                                "texture_height=1e-4,texture_wavelength=2e-3");
 }
 
+void write_traces(const fs::path& folder) {
+  std::array<tactree::telemetry::Tick, 2> ticks;
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    ticks[i].time_us = 1000 * i;
+    ticks[i].telemetry.header.tick = static_cast<std::uint32_t>(i);
+    ticks[i].telemetry.state = static_cast<std::uint32_t>(tactree::core::State::kActive);
+  }
+  for (const char* const name : {"trace.csv", "trace.npz"}) {
+    const auto file = tactree::telemetry::open_tick_file(folder / name);
+    file->append(ticks);
+    file->finish();
+  }
+}
+
 void write_rows(const fs::path& folder) {
   write(folder / "points", "x,y,z\n# a remark\n0.1,0.2,0.3\n1e-3;2;+3\n\n");
   write(folder / "path", "t_s,x,y,z\n0,0,0,0.01\n0.2,0,0,-0.002\n1 0 0 -0.002\n");
@@ -484,7 +501,7 @@ int main(int argc, char** argv) {
     fs::remove_all(folder);
     fs::create_directories(folder / "open_blob");
     for (const char* name : {"import_mesh", "read_scan", "read_device", "read_firmware",
-                             "read_materials", "read_rows", "read_scene"}) {
+                             "read_materials", "read_rows", "read_scene", "read_trace"}) {
       fs::create_directories(folder / name);
     }
     write_valid_blobs(folder / "open_blob");
@@ -497,6 +514,7 @@ int main(int argc, char** argv) {
     write_firmware(folder / "read_firmware");
     write_materials(folder / "read_materials");
     write_rows(folder / "read_rows");
+    write_traces(folder / "read_trace");
     write_scenes(folder / "read_scene");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "make_seeds: %s\n", error.what());

@@ -50,4 +50,21 @@ class MemoryFile {
   int descriptor_;
 };
 
+/// A folder of this process.
+class Folder {
+ public:
+  Folder() {
+    std::string name = std::filesystem::temp_directory_path() / "fuzz-XXXXXX";
+    require(::mkdtemp(name.data()) != nullptr, "no folder can be made");
+    path_ = name;
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
 }  // namespace tactree::fuzz

@@ -19,6 +19,7 @@
 #include "tactree/setup/scene_file.hpp"
 #include "tactree/simulation/injection.hpp"
 #include "tactree/support/device_file.hpp"
+#include "tactree/viewer/trace_playback.hpp"
 
 namespace {
 
@@ -79,6 +80,9 @@ TEST(Seeds, ReadsCommandLineFiles) {
   EXPECT_EQ(tactree::setup::read_scene(scenes / "moving", {blob}).bodies.size(), 1U);
   EXPECT_EQ(tactree::cli::read_points(tactree::test::seeds_folder() / "read_rows/points").size(),
             2U);
+  for (const fs::path& file : seeds_of("read_trace")) {
+    EXPECT_EQ(tactree::viewer::read_trace(file).size(), 2U) << file;
+  }
   EXPECT_GE(seeds_of("read_rows").size(), 2U + tactree::simulation::injection_kinds().size());
 }
 

@@ -93,6 +93,10 @@ std::vector<Member> all_members() {
   return members;
 }
 
+bool is_float(double value) {
+  return std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max());
+}
+
 core::State state_of(std::string_view name) {
   for (std::uint32_t i = 0; i < core::kStates; ++i) {
     if (name == core::name_of(static_cast<core::State>(i))) {
@@ -141,7 +145,11 @@ std::vector<Sample> read_csv(const std::filesystem::path& file) {
   while (table.next_row()) {
     Sample sample = blank_sample(has_parts);
     for (const auto& [column, member] : members) {
-      member.set(sample, table.number(column));
+      const double value = table.number(column);
+      if (!is_float(value)) {
+        table.refuse(member.column + " is not a float32 number", kRemedy);
+      }
+      member.set(sample, value);
     }
     sample.status.state = state ? state_of(table.cells()[*state]) : core::State::kBoot;
     if (!has_tip) {
@@ -170,8 +178,8 @@ void set_all(const telemetry::NpzReader& archive, const Member& member,
                    fmt::format("{} values instead of {}", values.size(), samples.size()));
   }
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (!std::isfinite(values[i])) {
-      archive.refuse(member.column, fmt::format("row {} is not finite", i));
+    if (!is_float(values[i])) {
+      archive.refuse(member.column, fmt::format("row {} is not a finite float32 number", i));
     }
     member.set(samples[i], values[i]);
   }
