@@ -57,17 +57,18 @@ TEST(Gaps, FindsHolePositionAndSize) {
 // Where a random cloud is less dense than the spacing requires, the border points of its voids lie
 // beside each other.
 TEST(Gaps, AreAbsentInSparseRandomCloud) {
-  const auto per_spacing = 1.45;
-  const auto count = static_cast<std::size_t>(per_spacing * 4.0 * std::numbers::pi * 60.0 * 60.0);
+  constexpr double kPerSquareSpacing = 1.6;
+  const auto count =
+      static_cast<std::size_t>(kPerSquareSpacing * 4.0 * std::numbers::pi * 60.0 * 60.0);
   const Gaps gaps = find_gaps(resampled(random_sphere(count, 0.06)), kSpacing, kRadius);
   EXPECT_TRUE(gaps.openings.empty()) << gaps.openings.size();
   EXPECT_LT(gaps.largest_m, kBridgedSpacings * kSpacing);
 }
 
 TEST(Gaps, OmitsHolesThatAreBridged) {
-  const Gaps gaps = find_gaps(sphere_with_hole(0.003), kSpacing, kRadius);
+  const Gaps gaps = find_gaps(sphere_with_hole(0.0032), kSpacing, kRadius);
   EXPECT_TRUE(gaps.openings.empty());
-  EXPECT_NEAR(gaps.largest_m, 0.003, 0.7 * kSpacing);
+  EXPECT_NEAR(gaps.largest_m, 0.0032, 0.6 * kSpacing);
 }
 
 TEST(Gaps, ClassifiesSheetBorderAsBoundary) {
