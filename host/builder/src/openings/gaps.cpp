@@ -27,8 +27,6 @@ constexpr double kBehindSpacings = 0.3;
 constexpr double kGoesOnSpacings = 1.0;
 // Distance of an empty ball from the point beside it.
 constexpr double kBesideSpacings = 0.85;
-// Average distance of border points from the edge of a hole, summed over both sides.
-constexpr double kStandBackSpacings = 0.5;
 // Border points belong to one opening if they are close to each other and their `away` directions
 // agree, or if the points at the look distance into the opening are close to each other. The latter
 // joins opposite sides of a small hole. Distances in support radii.
@@ -42,7 +40,9 @@ constexpr double kAcrossCosine = 0.707;
 constexpr double kHolePart = 0.5;
 constexpr std::size_t kLooks = 64;
 constexpr double kBridgedRadii = kBridgedSpacings / kSupportSpacings;
-constexpr double kBallStepRadii = 0.25;  // between the centres of the balls that a point sees
+// An opening is wide if a slightly wider ball is empty: a border point touches it.
+constexpr double kWideRadii = 1.01 * kBridgedRadii;
+constexpr std::size_t kEnds = 32;  // of the border points of a hole, to measure its width between
 // Minimum number of border points per spacing of diameter; fewer are noise.
 constexpr double kLeastPointsPerSpacing = 1.0;
 constexpr std::size_t kLeastPoints = 6;  // of a hole wider than the radius, and of any edge
@@ -205,6 +205,13 @@ std::map<std::uint32_t, std::vector<std::uint32_t>> group(const ZOrderedCloud& b
   return groups;
 }
 
+/// Border points, and the surface that they belong to.
+struct Border {
+  ZOrderedCloud points;               // the normals are the directions away from the surface
+  std::vector<std::uint32_t> of_all;  // number of each in `all`
+  const ZOrderedCloud& all;
+};
+
 std::uint32_t farthest_from(const ZOrderedCloud& border, const std::vector<std::uint32_t>& members,
                             const Eigen::Vector3d& place) {
   return *std::max_element(members.begin(), members.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -213,73 +220,94 @@ std::uint32_t farthest_from(const ZOrderedCloud& border, const std::vector<std::
   });
 }
 
-// True if most border points face another border point across the opening. The normals of `border`
-// are the directions away from the surface.
+// True if two border points face each other across an opening. The normals of `border` are the
+// directions away from the surface.
+bool see_each_other(const ZOrderedCloud& border, std::uint32_t i, std::uint32_t j) {
+  const Eigen::Vector3d chord = border.positions()[j] - border.positions()[i];
+  const double cosine = kAcrossCosine * chord.norm();
+  return border.normals()[i].cast<double>().dot(chord) > cosine &&
+         border.normals()[j].cast<double>().dot(-chord) > cosine;
+}
+
+// True if most border points face another border point across the opening.
 bool is_hole(const ZOrderedCloud& border, const std::vector<std::uint32_t>& members) {
-  const auto sees = [&](std::uint32_t i, std::uint32_t j) {
-    const Eigen::Vector3d chord = border.positions()[j] - border.positions()[i];
-    const double cosine = kAcrossCosine * chord.norm();
-    return border.normals()[i].cast<double>().dot(chord) > cosine &&
-           border.normals()[j].cast<double>().dot(-chord) > cosine;
-  };
   const std::size_t stride = 1 + (members.size() - 1) / kLooks;
   std::size_t looks = 0;
   std::size_t met = 0;
   for (std::size_t k = 0; k < members.size(); k += stride, ++looks) {
     const std::uint32_t i = members[k];
-    met += std::any_of(members.begin(), members.end(), [&](std::uint32_t j) { return sees(i, j); })
+    met += std::any_of(members.begin(), members.end(),
+                       [&](std::uint32_t j) { return see_each_other(border, i, j); })
                ? 1U
                : 0U;
   }
   return static_cast<double>(met) > kHolePart * static_cast<double>(looks);
 }
 
-/// Border points, and the surface that they belong to.
-struct Border {
-  ZOrderedCloud points;               // the normals are the directions away from the surface
-  std::vector<std::uint32_t> of_all;  // number of each in `all`
-  const ZOrderedCloud& all;
-};
-
-// Diameter of the widest ball without points of this side of the body, up to `most`, whose centre
-// lies before a border point.
-double widest_ball(const Border& border, const std::vector<std::uint32_t>& members, double radius,
-                   double most) {
-  double widest = 0.0;
-  const std::size_t stride = 1 + (members.size() - 1) / kLooks;
-  for (std::size_t k = 0; k < members.size(); k += stride) {
-    const std::uint32_t i = members[k];
-    const Eigen::Vector3f& normal = border.all.normals()[border.of_all[i]];
-    for (double ahead = kBallStepRadii * radius; ahead < 0.5 * most + kBallStepRadii * radius;
-         ahead += kBallStepRadii * radius) {
-      const Eigen::Vector3d centre =
-          border.points.positions()[i] + ahead * border.points.normals()[i].cast<double>();
-      double squared = ahead * ahead;
-      border.all.visit_within(centre, ahead, [&](std::uint32_t j, double its) {
-        if (its < squared && normal.dot(border.all.normals()[j]) > kOtherSideCosine) {
-          squared = its;
-        }
-      });
-      widest = std::max(widest, 2.0 * std::sqrt(squared));
+// Diameter of the ball around `centre`, up to `most`, without points of the side of the body that
+// border point `i` is on.
+double empty_ball(const Border& border, std::uint32_t i, const Eigen::Vector3d& centre,
+                  double most) {
+  const Eigen::Vector3f& normal = border.all.normals()[border.of_all[i]];
+  double squared = 0.25 * most * most;
+  border.all.visit_within(centre, 0.5 * most, [&](std::uint32_t j, double its) {
+    if (its < squared && normal.dot(border.all.normals()[j]) > kOtherSideCosine) {
+      squared = its;
     }
-  }
-  return std::min(widest, most);
+  });
+  return 2.0 * std::sqrt(squared);
 }
 
-Opening measure(const ZOrderedCloud& border, const std::vector<std::uint32_t>& members,
-                double spacing) {
+// Width of a hole: diameter of the widest empty ball midway between two border points that face
+// each other.
+double width_of_hole(const Border& border, const std::vector<std::uint32_t>& members) {
+  const std::vector<Eigen::Vector3d>& positions = border.points.positions();
+  const std::size_t stride = 1 + (members.size() - 1) / kEnds;
+  double widest = 0.0;
+  for (std::size_t a = 0; a < members.size(); a += stride) {
+    for (std::size_t b = a + stride; b < members.size(); b += stride) {
+      const std::uint32_t i = members[a];
+      const std::uint32_t j = members[b];
+      const double most = (positions[i] - positions[j]).norm();
+      if (most > widest && see_each_other(border.points, i, j)) {
+        const Eigen::Vector3d middle = 0.5 * (positions[i] + positions[j]);
+        widest = std::max(widest, empty_ball(border, i, middle, most));
+      }
+    }
+  }
+  return widest;
+}
+
+// Diameter, up to `most`, of the widest empty ball that touches a border point from outside.
+double width_beyond(const Border& border, const std::vector<std::uint32_t>& members, double most) {
+  const std::size_t stride = 1 + (members.size() - 1) / kLooks;
+  double widest = 0.0;
+  for (std::size_t k = 0; k < members.size(); k += stride) {
+    const std::uint32_t i = members[k];
+    const Eigen::Vector3d beyond =
+        border.points.positions()[i] + 0.5 * most * border.points.normals()[i].cast<double>();
+    widest = std::max(widest, empty_ball(border, i, beyond, most));
+  }
+  return widest;
+}
+
+Opening measure(const Border& border, const std::vector<std::uint32_t>& members) {
+  const std::vector<Eigen::Vector3d>& positions = border.points.positions();
   Opening opening;
   opening.points = static_cast<std::uint32_t>(members.size());
   for (const std::uint32_t i : members) {
-    opening.centre += border.positions()[i];
+    opening.centre += positions[i];
   }
   opening.centre /= static_cast<double>(members.size());
-  const bool hole = is_hole(border, members);
-  opening.kind = hole ? Opening::Kind::kHole : Opening::Kind::kBoundary;
-  const std::uint32_t one = farthest_from(border, members, opening.centre);
-  const std::uint32_t other = farthest_from(border, members, border.positions()[one]);
-  const double across = (border.positions()[one] - border.positions()[other]).norm();
-  opening.diameter_m = std::max(0.0, across - (hole ? kStandBackSpacings * spacing : 0.0));
+  if (is_hole(border.points, members)) {
+    opening.kind = Opening::Kind::kHole;
+    opening.diameter_m = width_of_hole(border, members);
+  } else {
+    opening.kind = Opening::Kind::kBoundary;
+    const std::uint32_t one = farthest_from(border.points, members, opening.centre);
+    const std::uint32_t other = farthest_from(border.points, members, positions[one]);
+    opening.diameter_m = (positions[one] - positions[other]).norm();
+  }
   return opening;
 }
 
@@ -330,21 +358,19 @@ Gaps find_gaps(const ZOrderedCloud& points, double spacing, double radius, bool 
   }
   Border border{points.subset(at_border), std::move(at_border), points};
   border.points.set_normals(std::move(directions));
-  const double bridged = kBridgedRadii * radius;
   for (const auto& [root, members] : group(border.points, radius)) {
-    Opening opening = measure(border.points, members, spacing);
+    const Opening opening = measure(border, members);
     if (members.size() < kLeastPoints || static_cast<double>(members.size()) * spacing <
                                              kLeastPointsPerSpacing * opening.diameter_m) {
       continue;
     }
-    const bool hole = opening.kind == Opening::Kind::kHole;
-    const double most = hole ? opening.diameter_m : std::min(opening.diameter_m, 2.0 * radius);
-    const double ball = widest_ball(border, members, radius, most);
-    if (hole) {
-      opening.diameter_m = ball;
-      gaps.largest_m = std::max(gaps.largest_m, ball);
+    double width = opening.diameter_m;
+    if (opening.kind == Opening::Kind::kHole) {
+      gaps.largest_m = std::max(gaps.largest_m, width);
+    } else {
+      width = std::min(width, width_beyond(border, members, kWideRadii * radius));
     }
-    if (ball > bridged) {
+    if (width > kBridgedRadii * radius) {
       gaps.openings.push_back(opening);
     }
   }

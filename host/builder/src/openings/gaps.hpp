@@ -16,9 +16,9 @@ struct Gaps {
 /// A point is a border point if its neighbours leave a wedge of 120 degrees of its tangent plane
 /// empty, the central part of the wedge holds no point within `radius`, and the surface does not
 /// turn there at an edge or around the edge of a plate thinner than `radius`. Adjacent border
-/// points form an opening: a hole if their wedges face each other, otherwise a boundary. An opening
-/// is as wide as the widest ball without points that its border points see: the border points of
-/// voids of a random cloud lie beside each other as well. Finds holes from 1.2 radii; their
+/// points form an opening: a hole if their wedges face each other, otherwise a boundary. A hole
+/// is as wide as the widest ball without points between its border points: those of the voids of a
+/// random cloud may lie beside each other in a long row. Finds holes from 1.2 radii; their
 /// diameter is accurate to about one spacing. `watertight` means that the points were sampled from
 /// a closed mesh, which has no openings. `radius` is that of the surface fit, 2.5 spacings.
 /// Deterministic. Cost: about 5 us per point and core.
