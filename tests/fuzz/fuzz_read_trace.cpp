@@ -15,13 +15,10 @@ namespace {
 
 using namespace tactree;
 
-bool is_finite(const core::Vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 void repeat(const std::vector<simulation::Sample>& samples) {
   try {
-    for (const simulation::Waypoint& waypoint : simulation::repeated_path(samples).waypoints()) {
+    const simulation::HandPath path = simulation::repeated_path(samples);
+    for (const simulation::Waypoint& waypoint : path.waypoints()) {
       fuzz::require(std::isfinite(waypoint.t_s) && waypoint.position_m.allFinite(),
                     "a waypoint is not finite");
     }
@@ -36,8 +33,9 @@ void examine(const std::filesystem::path& file) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
       fuzz::require(std::isfinite(samples[i].t_s), "a time is not finite");
       fuzz::require(i == 0 || samples[i].t_s > samples[i - 1].t_s, "the time does not ascend");
-      fuzz::require(is_finite(samples[i].status.probe) && is_finite(samples[i].status.force),
-                    "a position or force is not finite");
+      fuzz::require(
+          core::is_finite(samples[i].status.probe) && core::is_finite(samples[i].status.force),
+          "a position or force is not finite");
     }
     repeat(samples);
   } catch (const std::runtime_error& error) {
