@@ -412,6 +412,7 @@ void write_traces(const fs::path& folder) {
   for (std::size_t i = 0; i < ticks.size(); ++i) {
     ticks[i].time_us = 1000 * i;
     ticks[i].telemetry.header.tick = static_cast<std::uint32_t>(i);
+    ticks[i].telemetry.header.fields = tactree::telemetry::kRecordedFields;
     ticks[i].telemetry.state = static_cast<std::uint32_t>(tactree::core::State::kActive);
   }
   for (const char* const name : {"trace.csv", "trace.npz"}) {
