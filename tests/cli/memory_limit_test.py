@@ -41,7 +41,7 @@ class MemoryLimit(ToolFolder):
         self.build_large("--threads", "1")
         self.assertEqual(pathlib.Path(self.path, "o.blob").read_bytes(), one)
 
-    def test_wide_spacing_takes_a_fifth_of_the_memory(self):
+    def test_wide_spacing_takes_a_quarter_of_the_memory(self):
         points = 400_000
         self.write("large.xyz", sphere(points, 0.05))
         mean_distance = (4 * math.pi / points) ** 0.5 * 0.05

@@ -387,7 +387,7 @@ class Pipeline {
 
 // A build at the spacing of the cloud takes this much for each point of the scan; at wider ones it
 // takes less.
-constexpr std::uint64_t kBytesPerPoint = 280;
+constexpr std::uint64_t kBytesPerPoint = 220;
 constexpr std::uint64_t kProgramBytes = 24U << 20U;  // without points
 constexpr std::uint64_t kLeastPoints = 1000;
 

@@ -167,7 +167,7 @@ class BuildError : public std::runtime_error {
 };
 
 /// Reads the files and builds one model from all of them. Throws ReadError or BuildError.
-/// Cost: about 2 us per input point and 20 us per output point on two cores, and up to 280 bytes
+/// Cost: about 2 us per input point and 20 us per output point on two cores, and up to 220 bytes
 /// per input point.
 [[nodiscard]] BuildResult build_model(std::span<const std::filesystem::path> inputs,
                                       const BuildOptions& options, Progress& progress);
