@@ -274,7 +274,7 @@ void add_slides(Page& page, const std::vector<ScanResult>& scans) {
       "holes, and where a part is thinner than the depth. *Step*: change of the force between two "
       "ticks, less the change that is\n"
       "due to the movement of the hand. *Late*: crossings noticed deeper than 1 mm, in one of the "
-      "next two ticks. *Missed*: the others.\n"
+      "next two ticks.\n*Missed*: the others.\n"
       "\n"
       "| model | ticks | lost | force, N | step, N, 99 % | 99.9 % | largest | crossings | late | "
       "missed |\n"
