@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 
 #include "geometry/disjoint_sets.hpp"
 #include "geometry/local_points.hpp"
@@ -42,7 +43,6 @@ constexpr std::size_t kLooks = 64;
 constexpr double kBridgedRadii = kBridgedSpacings / kSupportSpacings;
 // An opening is wide if a slightly wider ball is empty: a border point touches it.
 constexpr double kWideRadii = 1.01 * kBridgedRadii;
-constexpr std::size_t kEnds = 32;  // of the border points of a hole, to measure its width between
 // Minimum number of border points per spacing of diameter; fewer are noise.
 constexpr double kLeastPointsPerSpacing = 1.0;
 constexpr std::size_t kLeastPoints = 6;  // of a hole wider than the radius, and of any edge
@@ -259,19 +259,28 @@ double empty_ball(const Border& border, std::uint32_t i, const Eigen::Vector3d& 
 }
 
 // Width of a hole: diameter of the widest empty ball midway between two border points that face
-// each other.
+// each other. From each point, the nearest one that it sees finds the width of a crack, and the
+// farthest one that of a round hole.
 double width_of_hole(const Border& border, const std::vector<std::uint32_t>& members) {
   const std::vector<Eigen::Vector3d>& positions = border.points.positions();
-  const std::size_t stride = 1 + (members.size() - 1) / kEnds;
+  const std::size_t stride = 1 + (members.size() - 1) / kLooks;
   double widest = 0.0;
-  for (std::size_t a = 0; a < members.size(); a += stride) {
-    for (std::size_t b = a + stride; b < members.size(); b += stride) {
-      const std::uint32_t i = members[a];
-      const std::uint32_t j = members[b];
-      const double most = (positions[i] - positions[j]).norm();
-      if (most > widest && see_each_other(border.points, i, j)) {
-        const Eigen::Vector3d middle = 0.5 * (positions[i] + positions[j]);
-        widest = std::max(widest, empty_ball(border, i, middle, most));
+  for (std::size_t k = 0; k < members.size(); k += stride) {
+    const std::uint32_t i = members[k];
+    std::optional<Neighbour> nearest;
+    std::optional<Neighbour> farthest;
+    for (const std::uint32_t j : members) {
+      if (see_each_other(border.points, i, j)) {
+        const Neighbour seen{(positions[j] - positions[i]).squaredNorm(), j};
+        nearest = nearest ? std::min(*nearest, seen) : seen;
+        farthest = farthest ? std::max(*farthest, seen) : seen;
+      }
+    }
+    for (const std::optional<Neighbour>& other : {nearest, farthest}) {
+      if (other && other->squared_distance > widest * widest) {
+        const Eigen::Vector3d middle = 0.5 * (positions[i] + positions[other->index]);
+        widest =
+            std::max(widest, empty_ball(border, i, middle, std::sqrt(other->squared_distance)));
       }
     }
   }

@@ -71,6 +71,23 @@ TEST(Gaps, OmitsHolesThatAreBridged) {
   EXPECT_NEAR(gaps.largest_m, 0.0032, 0.6 * kSpacing);
 }
 
+// A row of border points on either side, of which only those opposite each other show its width.
+TEST(Gaps, FindsLongCrack) {
+  Cloud sheet;
+  for (int x = -460; x <= 460; ++x) {
+    for (int y = -20; y <= 20; ++y) {
+      if (std::abs(x) > 420 || std::abs(y) > 2) {
+        sheet.positions.emplace_back(1e-3 * x, 1e-3 * y, 0.0);
+        sheet.normals.push_back(Eigen::Vector3f::UnitZ());
+      }
+    }
+  }
+  const Gaps gaps = find_gaps(ZOrderedCloud(std::move(sheet)), kSpacing, kRadius);
+  ASSERT_EQ(gaps.openings.size(), 2U);  // and the boundary
+  EXPECT_EQ(gaps.openings[1].kind, Opening::Kind::kHole);
+  EXPECT_NEAR(gaps.openings[1].diameter_m, 0.006, 0.5 * kSpacing);
+}
+
 TEST(Gaps, ClassifiesSheetBorderAsBoundary) {
   Cloud sheet = cosine_sheet(160, 0.06, 0.001, 150.0);
   for (const Eigen::Vector3d& p : sheet.positions) {
