@@ -4,7 +4,6 @@
 // checksums that a fuzzer cannot guess.
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
